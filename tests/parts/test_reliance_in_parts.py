@@ -19,7 +19,7 @@ from rosprivacy.parts.crossings import Beyond, Crossroads
 from rosprivacy.parts.distributed import analyse_in_parts
 from rosprivacy.settings import Settings
 from rosprivacy.systems.fleet_system import answer_fleet
-from tests.analysis.whatif.test_reliance import One, by_brute_force
+from tests.helpers.brute_reliance import StatementKey, reliance_by_brute_force
 from tests.helpers.fleet_files import policy, write
 from tests.helpers.parts import in_list, question, scattered
 from tests.helpers.random_fleets import Case, fleets
@@ -76,7 +76,7 @@ def test_the_rows_are_those_of_one_graph(case: Case, size: int) -> None:
         assert in_parts(case, size) == memory[1]
 
 
-def named(row: Reliance) -> One:
+def named(row: Reliance) -> StatementKey:
     """The statement, and the names of what it is about, which are the same on all robots."""
     return (row.statement, row.elements[0].name, *sorted({element.name for element in row.to}))
 
@@ -88,7 +88,7 @@ def test_the_rows_are_those_of_brute_force(case: Case) -> None:
         return
     placed = memory[0]
     rows = {named(row): row for row in in_parts(case, 1)}
-    for lost, expected in by_brute_force(placed.graph, placed.bound, HIERARCHY, Options()).items():
+    for lost, expected in reliance_by_brute_force(placed.graph, placed.bound, HIERARCHY, Options()).items():
         row = rows.get(lost)
         if expected is None:
             assert row is None or row.refused, lost

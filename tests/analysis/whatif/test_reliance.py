@@ -12,75 +12,20 @@ from hypothesis import strategies as st
 from rosprivacy.analysis.errors import InputErrors
 from rosprivacy.analysis.example import ARCHIVE, CAMERA, DISK, FACES, FILTER, FILTERED, ROSOUT, factory
 from rosprivacy.analysis.findings.findings import Options, analyse
-from rosprivacy.analysis.model import GLOB, NOWHERE, Place, Statement
+from rosprivacy.analysis.model import GLOB, Place, Statement
 from rosprivacy.analysis.whatif import reliance
 from rosprivacy.analysis.whatif.reliance import Opening, Reliance, reliances
 from rosprivacy.analysis.whatif.spots import BRINGS_IN
+from tests.helpers.brute_reliance import StatementKey, reliance_by_brute_force
 from tests.helpers.lined_systems import stated
 from tests.helpers.more_systems import ranked, wildcards
 from tests.helpers.systems import systems
 
 if TYPE_CHECKING:
-    from rosprivacy.analysis.answer import Analysis
     from rosprivacy.analysis.case import Case
-    from rosprivacy.analysis.model import Bound, FlowGraph
-
-Found = dict[tuple[str, ...], tuple[bool, bool]]
-One = tuple[Any, ...]
 
 
-def answered(analysis: Analysis) -> tuple[Found, set[tuple[Any, str]]]:
-    """Finding that nobody accepted -> (it stands, plain data is in it), with what stands beside it; open questions."""
-    found: dict[Any, tuple[bool, bool]] = {}
-    beside = {f.id: f for f in analysis.findings if f.plain_also}
-    also = {(f.kind, f.category, f.source, f.leak) for f in beside.values()}
-    for f in analysis.findings:
-        key = (f.kind, f.category, f.source, f.leak)
-        if not f.plain_also and not f.accepted:
-            found[key] = (f.stands, not f.pseudonymised or key in also)
-    return found, {(q.element.shown_as, c) for q in analysis.open for c in q.categories}
-
-
-def one(statement: Statement, graph: FlowGraph, *ends: int) -> One:
-    """A glob is one statement with all that it is about; a name is one for each name."""
-    return (statement, *(() if statement.glob else (graph.elements[v].name for v in ends)))
-
-
-def without(graph: FlowGraph, bound: Bound, lost: One) -> Bound:
-    ends = [(flow.source, flow.target) for flow in graph.flows]
-    return replace(
-        bound,
-        elements={v: tuple(s for s in said if one(s, graph, v) != lost) for v, said in bound.elements.items()},
-        flows={i: tuple(s for s in said if one(s, graph, *ends[i]) != lost) for i, said in bound.flows.items()},
-    )
-
-
-def by_brute_force(graph: Any, bound: Bound, hierarchy: Any, options: Options) -> dict[One, Any]:
-    """Statement -> what comes about without it; None where the labels contradict each other then."""
-    before, asked = answered(analyse(graph, bound, hierarchy, options))
-    result: dict[One, Any] = {}
-    at = [((v,), said) for v, said in bound.elements.items()]
-    along = [((graph.flows[i].source, graph.flows[i].target), said) for i, said in bound.flows.items()]
-    for ends, said in (*at, *along):
-        for statement in said:
-            if statement.role in BRINGS_IN or statement.place == NOWHERE:
-                continue
-            key = one(statement, graph, *ends)
-            try:
-                after, questions = answered(analyse(graph, without(graph, bound, key), hierarchy, options))
-            except InputErrors:
-                result[key] = None
-                continue
-            worse = {
-                key: state
-                for key, state in after.items()
-                if key not in before or any(now and not then for now, then in zip(state, before[key], strict=True))
-            }
-            result[key] = (worse, questions - asked)
-    return result
-
-
-def named(row: Reliance) -> One:
+def named(row: Reliance) -> StatementKey:
     """The same of a row; the sides of a wildcard have one name."""
     if row.statement.glob:
         return (row.statement,)
@@ -95,7 +40,7 @@ def compared(system: Any, options: Options) -> int:
     except InputErrors:
         return 0
     rows = {named(row): row for row in reliances(analysis, bound, hierarchy, options.accepts)}
-    for statement, expected in by_brute_force(graph, bound, hierarchy, options).items():
+    for statement, expected in reliance_by_brute_force(graph, bound, hierarchy, options).items():
         row = rows.get(statement)
         if expected is None:
             assert row is None or row.refused, statement  # where no data is, nobody is told
