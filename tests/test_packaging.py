@@ -78,8 +78,7 @@ def _answers(python: str) -> bool:
     return not subprocess.run([python, "-c", "import ensurepip"], capture_output=True, check=False).returncode
 
 
-MOST = 150_000_000  # bytes of the core and all that it needs, with the bytecode that pip makes; on x86_64
-LARGEST = {"3.11": 158_000_000}  # of all Pythons it writes the largest bytecode; the wheels bring 107 MB
+MOST = 150 * 2**20  # bytes of the core and all that it needs, with the bytecode that pip makes; on x86_64
 
 
 @pytest.mark.slow
@@ -101,8 +100,7 @@ def test_the_main_job_runs_in_a_fresh_environment_of_each_python(built: Path, tm
     subprocess.run(install, check=True, env=environment)
     (packages,) = tmp_path.glob("env/lib/python*/site-packages")
     assert (packages / "numpy" / "__pycache__").is_dir()
-    size = sum(path.lstat().st_size for path in packages.rglob("*"))  # as du -sb
-    assert size <= LARGEST.get(packages.parent.name.removeprefix("python"), MOST)
+    assert sum(path.lstat().st_size for path in packages.rglob("*") if path.is_file()) <= MOST
 
     def ran(*command: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)

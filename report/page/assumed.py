@@ -128,7 +128,7 @@ def _decisions(index: Index) -> Iterator[str]:
 
 def _standard(index: Index) -> str:
     taken = index.document["assumptions"]["standard_channels"]
-    if not taken:
+    if not taken or not index.document["standard_channels"]:
         return index.words("assumption.standard.none")
     channels = index.words.count(index.document["standard_channels"], "channel")
     said = {"channels": channels, "file": fit(taken["file"])}
