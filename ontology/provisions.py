@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from rdflib.term import Node
 
 FILES = ("law.ttl", "other_law.ttl")
-SIGNS = "(),.;:†‡§¶"  # beside the words of a citation
 MONTHS = 6  # after which a person has to look whether the law is still as it was read
 
 
@@ -98,13 +97,17 @@ def provisions_named(provisions: Iterable[Provision], words: str) -> tuple[Provi
     >>> [one.name for one in provisions_named(provisions("de"), "art. 32 dsgvo (sicherheit)")]
     ['Art. 32 DSGVO']
     """
-    wanted = {word.strip(SIGNS) for word in words.casefold().split()} - {""}
+    wanted = _bare_words(words)
 
     def name_words(provision: Provision) -> set[str]:
-        texts = (provision.identifier, provision.name, provision.title)
-        return {word.strip(SIGNS) for text in texts for word in text.casefold().split()}
+        return _bare_words(f"{provision.identifier} {provision.name} {provision.title}")
 
     return tuple(provision for provision in provisions if wanted <= name_words(provision))
+
+
+def _bare_words(text: str) -> set[str]:
+    signs = "".join({sign for sign in text if not sign.isalnum()})
+    return {word.strip(signs) for word in text.casefold().split()} - {""}
 
 
 def is_old(as_of: str, today: str) -> bool:

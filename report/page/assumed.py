@@ -142,7 +142,7 @@ def _stopped(index: Index) -> Iterator[str]:
     words, said = index.words, index.document["assumptions"]
     reached = said.get("standard_channels_reached", ())
     if reached:
-        names = index.names_and_nodes(row["element"] for row in reached)
+        names = index.names_by_node((row["element"] for row in reached), counted=True)
         yield words("assumption.standard.reached", names=words.row(names))
     if kept := [row for row in reached if row.get("keeps_from")]:
         yield words("assumption.standard.keeps", rows="; ".join(_kept_away(row, index) for row in kept))

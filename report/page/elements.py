@@ -163,7 +163,7 @@ def unreached_names(index: Index) -> tuple[tuple[str, int, tuple[str, ...]], ...
     """Return the elements that no data gets to: kind, number of names, names; of parameter services their number."""
     groups = grouped(index.document["unreached"], lambda element: element["kind"])
     return tuple(
-        (index.words.kind({"kind": some[0]["kind"]}), len(index.names(some)), index.names_and_nodes(some))
+        (index.words.kind({"kind": some[0]["kind"]}), len(index.names(some)), index.names_by_node(some, counted=True))
         for some in groups
     )
 

@@ -175,17 +175,16 @@ class Index:
         """Return the names of elements, each once; one that several robots have, with their number."""
         return names_of(elements, self.words, self.alike)
 
-    def names_by_node(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
-        """Return the same, where all parameter services of a node are one."""
+    def names_by_node(self, elements: Iterable[Mapping[str, Any]], *, counted: bool = False) -> tuple[str, ...]:
+        """Return the same, where all parameter services of a node are one; or, counted, those of all nodes."""
         nodes, others = whole_nodes(elements)
-        of_nodes = self.names({"robot": robot, "kind": "node", "name": node} for robot, node in nodes)
-        return (*([self.words("services", nodes=self.words.row(of_nodes))] if nodes else []), *self.names(others))
-
-    def names_and_nodes(self, elements: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
-        """Return the same, where parameter services are named by the number of their nodes alone."""
-        nodes, others = whole_nodes(elements)
-        number = self.words.count(weight((robot for robot, _ in nodes), self.alike), "node")
-        return (*([self.words("services", nodes=number)] if nodes else []), *self.names(others))
+        if counted:
+            of_nodes = self.words.count(weight((robot for robot, _ in nodes), self.alike), "node")
+        else:
+            of_nodes = self.words.row(
+                self.names({"robot": robot, "kind": "node", "name": node} for robot, node in nodes)
+            )
+        return (*([self.words("services", nodes=of_nodes)] if nodes else []), *self.names(others))
 
 
 def state(finding: Mapping[str, Any]) -> str:

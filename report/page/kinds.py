@@ -15,7 +15,7 @@ from rosprivacy.report.catalogs.words import spaced
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.naming import count_rows, text
 from rosprivacy.report.page.index import kind_anchor
-from rosprivacy.report.page.look_at import LookAt, context_of, of_kind
+from rosprivacy.report.page.look_at import LookAt, context_of, of_kind, unconfirmed_notes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -258,7 +258,7 @@ def provisions(entries: Iterable[KindEntry], further: FurtherLaw, index: Index) 
     return ProvisionList(
         usual,
         tuple(sorted(groups, key=lambda group: group.callers != "")),
-        tuple(sorted({look.unconfirmed for look in looks} - {""})),
+        unconfirmed_notes(looks),
     )
 
 

@@ -41,14 +41,19 @@ class LookAt(NamedTuple):
     applies: str
     unconfirmed: str
 
-    @property
-    def dates(self) -> str:
-        """All of it in a row."""
-        return "; ".join(filter(None, (self.reviewed, self.applies, self.unconfirmed)))
-
     def dates_but(self, usual: str) -> str:
         """When it was read, if not as most provisions, and from when on it applies."""
         return "; ".join(date for date in (self.reviewed, self.applies) if date not in ("", usual))
+
+
+def unconfirmed_notes(provisions: Iterable[LookAt]) -> tuple[str, ...]:
+    """Return what is not confirmed of some provisions, each note once, sorted.
+
+    >>> changed = LookAt("AI Act Art. 27", "", "", "2026-11-22", "", "amendment not confirmed")
+    >>> unconfirmed_notes([changed, changed._replace(unconfirmed="")])
+    ('amendment not confirmed',)
+    """
+    return tuple(sorted({provision.unconfirmed for provision in provisions} - {""}))
 
 
 class FurtherLaw(NamedTuple):

@@ -16,6 +16,7 @@ from markupsafe import Markup
 
 from rosprivacy.report.finding_facts import grouped
 from rosprivacy.report.page.html import environment_of, hashed, in_html
+from rosprivacy.report.page.look_at import unconfirmed_notes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -103,8 +104,8 @@ def _places(report: Outline) -> Iterator[CouncilPlace]:
 
 
 def _laws(laws: tuple[LookAt, ...], words: Words) -> CouncilLaws:
-    """What each says, without its title but where that is the name of a judgment; what several share is told once."""
-    notes = {note: MARK * number for number, note in enumerate(sorted({law.unconfirmed for law in laws} - {""}), 1)}
+    """What each says, with its title where that names an act or a judgment; what several share is told once."""
+    notes = {note: MARK * number for number, note in enumerate(unconfirmed_notes(laws), 1)}
     return CouncilLaws(
         tuple(
             CouncilLaw(
