@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
     from jinja2.bccache import Bucket
 
-_MARK = re.compile(r"(?<=[)}>])[:;](?= )")  # after a value or a tag
+_MARK = re.compile(r"(?<=[)}>])[:;](?=(?:\*\*)? )")  # after a value or a tag; bold may end there
 _BEFORE = {":": WIDE, ";": NARROW}
 TEMPLATE = ".j2"
 TEMPLATES = Path(__file__).parent / "templates"

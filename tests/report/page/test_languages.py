@@ -162,6 +162,7 @@ def test_french_spaces_keep_to_their_marks() -> None:
         assert "\u00a0:" in text
         assert "\\xa0" not in text
         assert "\\u202f" not in text
+        assert text.count(":** ") == text.count("\u00a0:** ")
     assert Words("fr").number(12345) == "12\u202f345"
 
 
